@@ -64,16 +64,16 @@ namespace limber
                 const dealii::Tensor<1, 3> &);
   template void
   stretches_along<2>(const MaterialBody<2> &,
-                  const PointView<2> &,
-                  std::size_t,
-                  const std::uint32_t *,
-                  const std::array<const double *, 2> &,
-                  double *);
+                     const PointView<2> &,
+                     std::size_t,
+                     const std::uint32_t *,
+                     const std::array<const double *, 2> &,
+                     double *);
   template void
   stretches_along<3>(const MaterialBody<3> &,
-                  const PointView<3> &,
-                  std::size_t,
-                  const std::uint32_t *,
-                  const std::array<const double *, 3> &,
-                  double *);
+                     const PointView<3> &,
+                     std::size_t,
+                     const std::uint32_t *,
+                     const std::array<const double *, 3> &,
+                     double *);
 } // namespace limber

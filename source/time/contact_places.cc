@@ -354,8 +354,8 @@ namespace limber
         finish_part<degree>();
         part.cell  = cell;
         part.field = field;
-        part.shares.assign(functions.n, 0.);
-        part.sizes.assign(functions.n, 0.);
+        std::fill_n(part.shares.begin(), functions.n, 0.);
+        std::fill_n(part.sizes.begin(), functions.n, 0.);
       }
     functions.go_to(of_body, candidate.point);
     functions.add_at_end_of(arm, weight, part.shares.data(), part.sizes.data());

@@ -20,12 +20,17 @@ namespace limber
 
 
 
+  // Friction acts in all directions: only where a place has none do these
+  // differ.
   template <int dim>
   void
-  ContactImpulses<dim>::find_relaxation()
+  ContactImpulses<dim>::find_borne()
   {
-    find_held();
     bears.assign(seen.size() * Borne::stride, 0.);
+    const bool differ =
+      std::any_of(places.begin(), places.end(), [](const Place &place) {
+        return !(place.friction > 0);
+      });
     for (std::size_t p = 0; p < places.size(); ++p)
       for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
         {
@@ -33,10 +38,27 @@ namespace limber
           const double  mass    = free_share(place, k) * place.mass;
           double *const of_node = &bears[shares.all[k].node * Borne::stride];
           of_node[Borne::all] += mass;
-          for (int d = 0; d < dim; ++d) // friction acts in all directions
-            of_node[Borne::along + d] +=
-              mass * (place.friction > 0 ? 1 : std::abs(place.normal[d]));
+          if (differ)
+            for (int d = 0; d < dim; ++d)
+              of_node[Borne::along + d] +=
+                mass * (place.friction > 0 ? 1 : std::abs(place.normal[d]));
         }
+    if (!differ)
+      for (std::size_t i = 0; i < seen.size(); ++i)
+        {
+          double *const of_node = &bears[i * Borne::stride];
+          std::fill_n(of_node + Borne::along, dim, of_node[Borne::all]);
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::find_relaxation()
+  {
+    find_held();
+    find_borne();
     if (!at_nodes && shares_nodes())
       {
         see_those_of_others();
@@ -57,7 +79,7 @@ namespace limber
 
     for (std::size_t p = 0; p < places.size(); ++p)
       {
-        double &sum = relative[p * lanes]; // s_p
+        double sum = 0; // s_p
         for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
           {
             PlaceShare &share = shares.all[k];
@@ -69,6 +91,7 @@ namespace limber
                    borne_along(places[p], share.node) *
                    inverse_mass[share.node];
           }
+        relative[p * lanes] = sum;
       }
     complete();
     for (std::size_t p = 0; p < places.size(); ++p)
@@ -137,12 +160,12 @@ namespace limber
   // with friction |a_pi|, as nodes are moved along the surface as well.
   template <int dim>
   double
-  ContactImpulses<dim>::free_share(const Place      &place,
-                                   const std::size_t share) const
+  ContactImpulses<dim>::share_beside_sides(const Place      &place,
+                                           const std::size_t share) const
   {
     const double        size = share_sizes[share];
     const std::uint32_t node = shares.all[share].node;
-    if (held_components.empty() || held_components[node] == 0)
+    if (held_components[node] == 0)
       return size;
     Vector free = place.normal;
     for (int d = 0; d < dim; ++d)

@@ -33,11 +33,11 @@ namespace limber
         for (int d = 0; d < dim; ++d)
           upwards[d] = surface.upwards[d].data();
         stretches_along<dim>(*parts.bodies[group.body],
-                        of_body,
-                        surface.points.size(),
-                        surface.points.data(),
-                        upwards,
-                        surface.stretch.data());
+                             of_body,
+                             surface.points.size(),
+                             surface.points.data(),
+                             upwards,
+                             surface.stretch.data());
         surface.add_to_fits(of_body, grid, corners.data(), fits.data());
       }
     share(fits_of_ranks, [this](const std::size_t t) {

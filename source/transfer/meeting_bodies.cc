@@ -173,12 +173,11 @@ namespace limber
       Number                  half_edge, reach;
 
       template <class Lanes>
-      __attribute__((always_inline))
-      PlacesOfPack(const PointView<dim> &points,
-                   const Lanes          &lanes,
-                   const double          inverse_density)
-        : half_edge(
-            half_edges_of<dim>(Number(lanes.load(points.mass) * inverse_density)))
+      __attribute__((always_inline)) PlacesOfPack(const PointView<dim> &points,
+                                                  const Lanes          &lanes,
+                                                  const double inverse_density)
+        : half_edge(half_edges_of<dim>(
+            Number(lanes.load(points.mass) * inverse_density)))
         , reach(half_edge)
       {
         for (int d = 0; d < dim; ++d)
@@ -186,7 +185,7 @@ namespace limber
         if (points.reach != nullptr)
           {
             const Number of_surface = lanes.load(points.reach);
-            reach = of_surface > 0. ? of_surface : half_edge;
+            reach                   = of_surface > 0. ? of_surface : half_edge;
           }
       }
 
@@ -349,7 +348,7 @@ namespace limber
                    std::vector<std::uint32_t> &near)
   {
     using Number       = PointPack<dim>;
-    const auto face_at  = [&](const std::uint32_t c) -> const Faces<dim>  &{
+    const auto face_at = [&](const std::uint32_t c) -> const Faces<dim> & {
       return faces[corners[c].slot / 2];
     };
     double            difference = 0; // of normals, squared
@@ -384,9 +383,8 @@ namespace limber
         // gap and the own reach; and of what is faced, that counts which is
         // less than its reach behind what is nearest. A quarter of an edge of
         // room is half of the way to the next row.
-        const Number furthest =
-          stretch * (2. * places.reach + largest_reach) +
-          (turned - 0.5) * places.half_edge;
+        const Number furthest = stretch * (2. * places.reach + largest_reach) +
+                                (turned - 0.5) * places.half_edge;
         for (int k = 0; k < pack.n; ++k)
           if (depth[k] <= furthest[k])
             near.push_back(static_cast<std::uint32_t>(pack.first + k));

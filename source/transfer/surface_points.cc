@@ -106,24 +106,26 @@ namespace limber
   template <int dim>
   void
   SurfacePoints<dim>::find(const PointView<dim> &of_body,
-                           const MeetingBatches &all)
+                           const MeetingBatches &meeting)
   {
     batches.clear();
     points.clear();
     if (of_body.reach == nullptr)
       return;
-    for (const MeetingBatch *some = all.begin; some != all.end; ++some)
+    for (const MeetingBatch *some = meeting.begin; some != meeting.end; ++some)
       {
         const std::size_t begin = points.size();
-        for (std::size_t p = some->batch.begin; p < some->batch.end; ++p)
-          if (is_at_surface(of_body, p))
-            points.push_back(static_cast<std::uint32_t>(p));
+        for (std::size_t p = some->batch.begin; p < some->batch.end; p += lanes)
+          {
+            if (usually(all(load<Number>(of_body.reach + p) <= 0.)))
+              continue;
+            for (std::size_t q = p; q < p + lanes && q < some->batch.end; ++q)
+              if (is_at_surface(of_body, q))
+                points.push_back(static_cast<std::uint32_t>(q));
+          }
         if (points.size() > begin)
-          batches.push_back({some->batch.cell,
-                             some->first,
-                             some->last,
-                             begin,
-                             points.size()});
+          batches.push_back(
+            {some->batch.cell, some->first, some->last, begin, points.size()});
       }
     // Packs may end beyond the last point.
     for (auto &component : upwards)
@@ -149,8 +151,8 @@ namespace limber
           std::array<Number, dim> mean{};
           for (std::uint32_t c = some.first; c < some.last; ++c)
             for (int d = 0; d < dim; ++d)
-              mean[d] += pack.functions[corners[c].k] *
-                         fits[corners[c].slot].guess()[d];
+              mean[d] +=
+                pack.functions[corners[c].k] * fits[corners[c].slot].guess()[d];
           Number square = mean[0] * mean[0];
           for (int d = 1; d < dim; ++d)
             square += mean[d] * mean[d];
@@ -182,8 +184,8 @@ namespace limber
           Number                  square{};
           for (int d = 0; d < dim; ++d)
             {
-              edge[d]  = 1 / grid.cells[some.cell].inverse_edge[d];
-              place[d] = pack.xi[d] * edge[d];
+              edge[d]              = 1 / grid.cells[some.cell].inverse_edge[d];
+              place[d]             = pack.xi[d] * edge[d];
               const auto component = load<Number>(&upwards[d][i]);
               square += component * component;
             }

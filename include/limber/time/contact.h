@@ -328,10 +328,11 @@ namespace limber
     struct Part
     {
       static constexpr std::uint32_t no_cell = invalid_cell;
+      static constexpr int n_nodes = dim == 2 ? 16 : 64; // of cubic splines
 
-      std::uint32_t       cell = no_cell;
-      unsigned int        field;
-      std::vector<double> shares, sizes; // of the nodes of the cell
+      std::uint32_t               cell = no_cell;
+      unsigned int                field;
+      std::array<double, n_nodes> shares, sizes; // of the nodes of the cell
     };
 
     const RunParts<dim> parts;

@@ -463,7 +463,15 @@ namespace limber
     double
     borne_along(const Place &place, std::uint32_t node) const;
     double
-    free_share(const Place &place, std::size_t share) const;
+    free_share(const Place &place, const std::size_t share) const
+    {
+      return held_components.empty() ? share_sizes[share] :
+                                       share_beside_sides(place, share);
+    }
+    double
+    share_beside_sides(const Place &place, std::size_t share) const;
+    void
+    find_borne();
     void
     find_relaxation();
     void

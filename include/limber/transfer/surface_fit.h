@@ -80,8 +80,8 @@ namespace limber
         const Number                  &reach,
         const Number                  &weight)
     {
-      const Number z = along(upwards, place) + reach;
-      const Number w = weight * exponential<Number>(z * inverse_edge);
+      const Number          z = along(upwards, place) + reach;
+      const Number          w = weight * exponential<Number>(z * inverse_edge);
       std::array<Number, n> all;
       all[0] = w;
       all[1] = w * z;
@@ -114,15 +114,15 @@ namespace limber
       if (!(sums[0] > 0))
         return upwards;
       // means, covariances and variances
-      const double                                   z = sums[1] / sums[0];
-      std::array<double, across>                     s, with_z;
+      const double               inverse = 1 / sums[0], z = inverse * sums[1];
+      std::array<double, across> s, with_z;
       std::array<std::array<double, across>, across> spread;
       for (int i = 0, k = 2; i < across; ++i)
         {
-          s[i]      = sums[k++] / sums[0];
-          with_z[i] = sums[k++] / sums[0] - s[i] * z;
+          s[i]      = inverse * sums[k++];
+          with_z[i] = inverse * sums[k++] - s[i] * z;
           for (int j = 0; j <= i; ++j)
-            spread[i][j] = spread[j][i] = sums[k++] / sums[0] - s[i] * s[j];
+            spread[i][j] = spread[j][i] = inverse * sums[k++] - s[i] * s[j];
         }
       std::array<double, across> beta;
       const double               least_variance = 0.05 * edge * edge;
@@ -136,8 +136,8 @@ namespace limber
         {
           const double mean = (spread[0][0] + spread[1][1]) / 2,
                        half = (spread[0][0] - spread[1][1]) / 2,
-                       root = std::sqrt(half * half +
-                                        spread[0][1] * spread[0][1]);
+                       root =
+                         std::sqrt(half * half + spread[0][1] * spread[0][1]);
           if (!(mean - root > least_variance))
             return upwards;
           const double determinant = (mean - root) * (mean + root);
@@ -168,9 +168,10 @@ namespace limber
     static Vector
     unit(Vector vector)
     {
-      const double square = along(vector, vector);
+      const double square  = along(vector, vector);
+      const double inverse = square > 0 ? 1 / std::sqrt(square) : 0;
       for (double &component : vector)
-        component *= square > 0 ? 1 / std::sqrt(square) : 0;
+        component *= inverse;
       return vector;
     }
 

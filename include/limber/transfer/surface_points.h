@@ -26,7 +26,7 @@ namespace limber
   struct SurfacePoints
   {
     std::vector<SurfaceBatch>            batches;
-    std::vector<std::uint32_t>           points; // their numbers in the body
+    std::vector<std::uint32_t>           points;  // their numbers in the body
     std::array<std::vector<double>, dim> upwards; // out of the body, of length
                                                   // 1, or 0 if nothing is known
     std::vector<double> stretch; // of the material in this direction

@@ -83,8 +83,8 @@ namespace
             place[0] = (i + 0.5) * edge;
             if constexpr (dim == 3)
               place[1] = (j + 0.5) * edge;
-            place[dim - 1]     = (k + 0.5) * edge;
-            double depth       = 0.03;
+            place[dim - 1] = (k + 0.5) * edge;
+            double depth   = 0.03;
             for (int d = 0; d < dim; ++d)
               depth -= place[d] * normal[d];
             if (depth > 0 && depth < edge * normal[dim - 1])
@@ -106,10 +106,12 @@ namespace
         // The heights are those along the guess, and the reaches are not: what
         // is left is of second order.
         const auto near =
-          fit_stairs<dim>(exact, sum(3, oblique<dim>(tangent + 0.02)), 3).normal();
+          fit_stairs<dim>(exact, sum(3, oblique<dim>(tangent + 0.02)), 3)
+            .normal();
         EXPECT_LT(distance<dim>(near, exact), 1e-3);
         EXPECT_NEAR(norm<dim>(near), 1, 1e-14);
-        EXPECT_LT(distance<dim>(fit_stairs<dim>(exact, exact, 3).normal(), exact),
+        EXPECT_LT(distance<dim>(fit_stairs<dim>(exact, exact, 3).normal(),
+                                exact),
                   1e-13);
       }
   }
@@ -127,9 +129,9 @@ TEST(SurfaceFit, FindsPlanesUnderStairs)
 
 TEST(SurfaceFit, HasNoOpinionOfFewPoints)
 {
-  const auto           guess = oblique<2>(0.3);
-  SurfaceFit<2>        fit(sum(2, guess), edge);
-  Vector<2>            place{};
+  const auto    guess = oblique<2>(0.3);
+  SurfaceFit<2> fit(sum(2, guess), edge);
+  Vector<2>     place{};
   EXPECT_EQ(fit.normal(), fit.guess());
   EXPECT_LT(distance<2>(fit.guess(), guess), 1e-15);
   fit.add(place, 0.05, 1.);
@@ -138,8 +140,8 @@ TEST(SurfaceFit, HasNoOpinionOfFewPoints)
   EXPECT_EQ(fit.normal(), fit.guess());
 
   // a row in three dimensions
-  SurfaceFit<3>        row(oblique<3>(0.3), edge);
-  Vector<3>            x{};
+  SurfaceFit<3> row(oblique<3>(0.3), edge);
+  Vector<3>     x{};
   for (int k = 0; k < 5; ++k)
     {
       x[0] = k * edge;
@@ -155,9 +157,9 @@ TEST(SurfaceFit, HasNoOpinionOfFewPoints)
 // The face below an edge is lower, however many points are next to it.
 TEST(SurfaceFit, LooksAtTheHighestFace)
 {
-  const Vector<2>      up{{0, 1}};
-  SurfaceFit<2>        fit(up, edge);
-  Vector<2>            place{};
+  const Vector<2> up{{0, 1}};
+  SurfaceFit<2>   fit(up, edge);
+  Vector<2>       place{};
   for (int k = 0; k < 6; ++k)
     {
       place[0] = -(k + 0.5) * edge;
