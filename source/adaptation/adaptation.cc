@@ -335,6 +335,7 @@ namespace limber
               }
             if (!any_here)
               break;
+            points.hand_over(); // parts of domains may lie in the next cell
           }
       }
     return any;

@@ -300,6 +300,26 @@ namespace limber
 
 
   template <int dim>
+  double
+  smallest_edge_with_points(const State<dim> &state)
+  {
+    double largest_inverse = 0;
+    for (const auto &body : state.bodies)
+      {
+        const PointView<dim> points = body->points.view();
+        for (std::size_t p = 0; p < points.size; ++p)
+          if (points.cell[p] != invalid_cell)
+            for (const double inverse :
+                 state.grid.geometry[points.cell[p]].inverse_edge)
+              largest_inverse = std::max(largest_inverse, inverse);
+      }
+    return 1 / dealii::Utilities::MPI::max(largest_inverse,
+                                           state.grid.communicator);
+  }
+
+
+
+  template <int dim>
   Symptoms
   find_symptoms(const State<dim> &state, const double signal_speed)
   {
@@ -317,7 +337,7 @@ namespace limber
 
     Symptoms symptoms;
     symptoms.courant_number =
-      state.step_size * signal_speed / state.grid.smallest_edge;
+      state.step_size * signal_speed / smallest_edge_with_points(state);
     symptoms.not_finite    = all.not_finite;
     symptoms.unseen_energy = unseen_share(all);
     for (std::size_t b = 0; b < state.bodies.size(); ++b)
@@ -333,6 +353,10 @@ namespace limber
 
 
 
+  template double
+  smallest_edge_with_points<2>(const State<2> &);
+  template double
+  smallest_edge_with_points<3>(const State<3> &);
   template Symptoms
   find_symptoms<2>(const State<2> &, double);
   template Symptoms

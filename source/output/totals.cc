@@ -13,6 +13,11 @@ namespace limber
     // Of a cell: lower bound of the energy scale, so that a liquid at rest does
     // not count as drifting when it is lifted by so little while points settle.
     constexpr double least_lift = 1e-4;
+
+    // Of the energy of the motion that outer forces have given the centre of
+    // mass, as gravity in free fall: the least inner scale. Nothing else may be
+    // there to compare with, and the fall has an error of its own.
+    constexpr double share_of_flight = 0.01;
   } // namespace
 
 
@@ -308,9 +313,15 @@ namespace limber
     const double given =
       inner - inner_energy(start.kinetic_energy, start.momentum, start.mass) +
       strain_change + losses;
-    start.inner_scale = std::max({start.inner_scale,
-                                  inner + std::abs(all.strain_energy),
-                                  std::abs(given)});
+    const dealii::Tensor<1, dim> impulse =
+      all.momentum + ledger.lost_momentum - start.momentum;
+    start.inner_scale =
+      std::max({start.inner_scale,
+                inner + std::abs(all.strain_energy),
+                std::abs(given),
+                start.mass > 0 ?
+                  share_of_flight * impulse.norm_square() / (2 * start.mass) :
+                  0});
     // Round-off of the energies, added up over the steps: of a body at rest
     // that of the potentials is more than all of its motion, of one in flight
     // that of the flight more than all of its vibration.
@@ -321,11 +332,13 @@ namespace limber
     // In a leapfrog scheme velocities belong to the middle of a step and places
     // to its end, which leaves this part of the potential undetermined: a fall
     // from rest would seem to lose 1 / (2 n + 1) of its energy after n steps.
+    // The last step may be shorter than those that gave the momentum.
+    const double mean_of_former =
+      state.step > 1 ? (state.time - state.step_size) / (state.step - 1.) : 0;
     const double of_half_a_step =
       moves_by_new_velocity(state.problem.method) ?
-        0.5 * state.step_size *
-          std::abs(state.problem.loads.gravity *
-                   (all.momentum + ledger.lost_momentum - start.momentum)) :
+        0.5 * std::max(state.step_size, mean_of_former) *
+          std::abs(state.problem.loads.gravity * impulse) :
         0;
     const double unknown      = round_off + of_half_a_step;
     const double beyond       = gain > unknown  ? gain - unknown :

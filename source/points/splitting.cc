@@ -288,7 +288,29 @@ namespace limber
         // column k: from one child to the next along edge k
         dealii::Tensor<2, dim> steps =
           2. / parts * half_edges(points, p, spacing);
-        for (int d = 0; d < dim; ++d)
+        const auto way_to = [&](const unsigned int child) {
+          dealii::Tensor<1, dim> way;
+          for (int k = 0, digits = child; k < dim; ++k, digits /= parts)
+            for (int d = 0; d < dim; ++d)
+              way[d] += (digits % parts - end) * steps[d][k];
+          return way;
+        };
+        const auto cell_at = [&](const dealii::Tensor<1, dim> &way) {
+          std::array<double, dim> x;
+          for (int d = 0; d < dim; ++d)
+            x[d] = points.place[d][p] + way[d];
+          return grid.bins.cell_at(x);
+        };
+        const auto all_have_cells = [&]() {
+          for (unsigned int child = 0; child < n_children; ++child)
+            if (cell_at(way_to(child)) == invalid_cell)
+              return false;
+          return true;
+        };
+        // Domains of children fill that of the point: where they overlap, they
+        // leave gaps elsewhere, and a body under stress creeps.
+        const bool may_leave_cell = points.has_domains() && all_have_cells();
+        for (int d = 0; d < dim && !may_leave_cell; ++d)
           {
             double all = 0;
             for (int k = 0; k < dim; ++k)
@@ -310,15 +332,10 @@ namespace limber
           if (component != nullptr)
             component[p] /= parts;
         ++size_classes[p];
-        const auto way_to = [&](const unsigned int child) {
-          dealii::Tensor<1, dim> way;
-          for (int k = 0, digits = child; k < dim; ++k, digits /= parts)
-            for (int d = 0; d < dim; ++d)
-              way[d] += (digits % parts - end) * steps[d][k];
-          return way;
-        };
         const auto place = [&](const std::size_t q, const unsigned int child) {
           const dealii::Tensor<1, dim> way = way_to(child);
+          if (may_leave_cell)
+            cell[q] = cell_at(way);
           shift_point(points, q, way, initial[i]);
           if (reach > 0)
             points.reach[q] =

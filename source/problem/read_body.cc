@@ -213,7 +213,7 @@ namespace limber
         meets.sides = any_hit && why_at_nodes(body, problem).empty();
         read_placement(section, meets, body, problem);
       }
-    warn_of_solid_motion(problem);
+    warn_of_solid_motion(root, problem);
     warn_of_unbounded_gradients(problem);
   }
 

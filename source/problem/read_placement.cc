@@ -208,6 +208,9 @@ namespace limber
      */
     constexpr double least_misfill = 0.02;
 
+    /** The same of a liquid, whose level and weight at rest are known. */
+    constexpr double least_misfill_of_liquid = 1e-3;
+
 
 
     /**
@@ -228,7 +231,7 @@ namespace limber
               !body.initial_stress && !meets.sides &&
               !(body.is_liquid && problem.grid.levels > 0) &&
               std::abs(filled_by_regular(block, body, problem.grid) - 1) <=
-                least_misfill);
+                (body.is_liquid ? least_misfill_of_liquid : least_misfill));
     }
 
 

@@ -58,6 +58,91 @@ namespace limber
 
 
     /**
+     * Cells that the mean initial velocity of a body carries it past until the
+     * end, if nothing stops it. Sampled on a lattice.
+     */
+    template <int dim>
+    double
+    cells_on_its_way(const Body<dim> &body, const Problem<dim> &problem)
+    {
+      if (body.initial_velocity.empty())
+        return 0;
+      constexpr unsigned int n   = 8;
+      const Corners<dim>     box = body.shape->bounding_box();
+      dealii::Tensor<1, dim> sum;
+      double                 count = 0;
+      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
+        {
+          dealii::Point<dim> place;
+          for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
+            place[d] = box.first[d] +
+                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
+          if (!body.shape->contains(place))
+            continue;
+          sum += body.initial_velocity.vector(place, 0);
+          ++count;
+        }
+      double result = 0;
+      for (unsigned int d = 0; d < dim && count > 0; ++d)
+        result = std::max(result,
+                          std::abs(sum[d]) / count * problem.end_time /
+                            problem.grid.edge(d));
+      return result;
+    }
+
+
+
+    /**
+     * Linear functions that the scene asks for, and a solid under load whose
+     * points will cross cells: it creeps with any transfer. ('auto' says itself
+     * why it takes linear functions.)
+     */
+    template <int dim>
+    void
+    warn_of_creep(const Section &root, Problem<dim> &problem)
+    {
+      const std::string word = root.subsection("Method").text("Kernel");
+      if (word == "auto" || problem.grid.kernel != KernelKind::linear)
+        return;
+      const std::string kernel =
+        problem.grid.against_splines.empty() ?
+          "'Method/Kernel = quadratic', or " :
+        problem.method.integration == TimeIntegration::explicit_steps &&
+            !is_affine(problem.method.transfer) ?
+          "'Method/Kernel = cpdi', or " :
+          "";
+      const Section loads      = root.subsection("Loads");
+      const auto    is_load_of = [&](const Body<dim>   &body,
+                                  const std::string &load) {
+        return loads.subsection("Face load " + load).text("Body") == body.name;
+      };
+      for (const Body<dim> &body : problem.bodies)
+        {
+          const bool keeps_strain =
+            !body.is_liquid && (!body.is_plastic || body.keeps_surface);
+          const auto   names     = loads.list("Face loads");
+          const bool   is_loaded = std::any_of(names.begin(),
+                                             names.end(),
+                                             [&](const std::string &load) {
+                                               return is_load_of(body, load);
+                                             });
+          const double cells     = cells_on_its_way(body, problem);
+          if (!keeps_strain || body.frame != Frame::current || !is_loaded ||
+              !(cells > 1.5))
+            continue;
+          problem.notes.push_back(
+            "Warning: body " + in_quotes(body.name) +
+            " is under load while it moves through about " +
+            brief(std::round(cells)) +
+            " cells: with linear functions it creeps at each. Set " + kernel +
+            "'Body " + body.name +
+            "/Frame = initial', if it touches no other body.");
+        }
+    }
+
+
+
+    /**
      * Mean angular velocity of the initial velocity of a body, about, 1/s.
      * Sampled on a lattice.
      */
@@ -323,8 +408,9 @@ namespace limber
 
   template <int dim>
   void
-  warn_of_solid_motion(Problem<dim> &problem)
+  warn_of_solid_motion(const Section &root, Problem<dim> &problem)
   {
+    warn_of_creep(root, problem);
     warn_of_bending_across_cells(problem);
     warn_of_torsion(problem);
     warn_of_rotation(problem);
@@ -345,7 +431,7 @@ namespace limber
   template bool
   bounds_gradients(const Body<3> &, const GridDescription<3> &);
   template void
-  warn_of_solid_motion(Problem<2> &);
+  warn_of_solid_motion(const Section &, Problem<2> &);
   template void
-  warn_of_solid_motion(Problem<3> &);
+  warn_of_solid_motion(const Section &, Problem<3> &);
 } // namespace limber

@@ -179,8 +179,9 @@ namespace limber
        "solids on cells of one size 'cut' if their faces run across the cells, or "
        "'regular' would miss the volume by more than 2 % (with several "
        "bodies, the faces); 'fitted' with domains, or linear functions and "
-       "contact; for liquids beside obstacles, with linear functions, 'cut', "
-       "unless they are boxes of whole parts"},
+       "contact; for liquids with linear functions 'cut', for boxes that "
+       "nothing may touch if 'regular' would miss the volume by more than 0.1 "
+       "%, beside obstacles unless they are boxes of whole parts"},
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss",
        Placement::gauss,

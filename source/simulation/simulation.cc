@@ -100,7 +100,7 @@ namespace limber
         const auto   speeds = integrator->state();
         const double number = integrator->longest_step() *
                               (speeds.wave_speed + speeds.point_speed) /
-                              grid.smallest_edge;
+                              smallest_edge_with_points(state);
         if (number > 1 + 1e-6)
           console.warn("The first step has Courant number " + brief(number) +
                        ": explicit steps beyond 1 become unstable. Set "

@@ -22,6 +22,12 @@ namespace limber
     // .03 g, with these .002 g.
     constexpr unsigned int passes_of_surfaces = 16;
 
+    // With friction and splines, accelerated. A spline sees several rows of
+    // points, and short waves of the impulses along the surface decay slowly:
+    // what four passes leave of them lets points slide that should stick, and
+    // does work on the body.
+    constexpr unsigned int passes_with_friction = 16;
+
 
 
     /** Distance of a place in the box from a side, m. */
@@ -196,7 +202,15 @@ namespace limber
       }
     if (cut_cells && cut_cells->any())
       return impulses.finish_adding({}, passes_of_surfaces);
-    impulses.finish_adding();
+    const bool may_stick =
+      is_spline(parts.problem.grid.kernel) &&
+      std::any_of(rigid.begin(), rigid.end(), [](const auto &obstacle) {
+        return obstacle.friction > 0 && std::isfinite(obstacle.friction);
+      });
+    if (may_stick)
+      impulses.finish_adding({}, passes_with_friction, /*hurry=*/true);
+    else
+      impulses.finish_adding();
   }
 
 

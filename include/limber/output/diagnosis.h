@@ -48,6 +48,12 @@ namespace limber
     bool        is_unstable = false; // stops runs and ejects points
   };
 
+  /** Smallest edge of the cells that hold points, m: the one that limits
+   * explicit steps. Collective. */
+  template <int dim>
+  double
+  smallest_edge_with_points(const State<dim> &state);
+
   /**
    * Evaluates the points; @p signal_speed: wave speed plus speed of the points,
    * m/s. Costs as much as some steps. Collective; only rank 0 gets an answer.

@@ -119,7 +119,9 @@ namespace limber
    * These terms depend on the frame of the observer. The inner scale does not:
    * T' + |U| with T' relative to the motion of the centre of mass, or |G| with
    * the work G of all outer forces beyond that on this motion, which is T' + U
-   * and all losses, minus the initial T' + U.
+   * and all losses, minus the initial T' + U; and it is at least a hundredth of
+   * the kinetic energy of the motion that outer forces have given the centre of
+   * mass, as in free fall.
    */
   template <int dim>
   class Balance

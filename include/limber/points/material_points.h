@@ -204,11 +204,13 @@ namespace limber
 
     /**
      * Split each of these points into @p parts (2 or 3) along each edge, side
-     * by side in its cell, which share its mass and otherwise copy it. So sums
-     * over points do not change, nor, with linear functions, those at nodes.
+     * by side, which share its mass and otherwise copy it. So sums over points
+     * do not change. The parts of a domain fill it, and may lie in cells around
+     * that of the point (also of other ranks); without domains they stay in its
+     * cell, so that with linear functions sums at nodes do not change either.
      * Initial positions, if stored, are shifted by a linear function of the
-     * position, fitted in the cell. Domains are divided likewise; @p spacing is
-     * that of points of size class 0, m, where there are none. The first of two
+     * position, fitted in the cell. @p spacing is that of points of size class
+     * 0, m, where there are no domains. The first of two
      * or the middle of three along each edge, which stays in place, keeps the
      * id, the others get ids from @p next_id on. For surface points with an
      * outward normal in @p normals (zero: unknown) no part sticks out: each

@@ -213,7 +213,7 @@ namespace limber
    */
   template <int dim>
   void
-  warn_of_solid_motion(Problem<dim> &problem);
+  warn_of_solid_motion(const Section &root, Problem<dim> &problem);
 
   /**
    * Whether points can have affine velocities with increments (AFLIP). With

@@ -76,6 +76,7 @@ namespace limber
       bool   is_given   = false; // the normal impulse, see give()
       double relaxation = 0;     // m_p / s_p, kg
       bool   sticks     = false;
+      Vector ahead; // J extrapolated to the next pass
 
       // For ContactLoss: a; b or r; the new velocity; K
       Vector increase, brought, after, held;
@@ -220,11 +221,13 @@ namespace limber
      * To be called after the last place has been added; masses of nodes are
      * known. Collective. @p peers lists, by rank, places with nodes on other
      * ranks. Four passes give the same results as sixteen for bodies that are
-     * pressed or roll.
+     * pressed or roll. With @p hurry passes are accelerated: sixteen are then
+     * worth some fifty.
      */
     void
     finish_adding(std::vector<Peer> &&peers  = {},
-                  unsigned int        passes = passes_of_points);
+                  unsigned int        passes = passes_of_points,
+                  bool                hurry  = false);
 
     static constexpr unsigned int passes_of_points = 4;
 
@@ -527,6 +530,7 @@ namespace limber
     std::vector<std::uint32_t> hanging; // 1 + place in the table, or 0
     std::vector<Peer>          peers;
     unsigned int               n_passes     = 0;
+    bool                       hurries      = false; // accelerated passes
     bool                       any_place    = false;
     bool                       at_nodes     = false; // finish_adding_nodes()
     bool                       holds_before = false; // in this step

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/adaptation/adaptation.h>
 #include <limber/base/exceptions.h>
+#include <limber/output/diagnosis.h>
 
 #include <gtest/gtest.h>
 #include <support/scene_parts.h>
@@ -685,6 +686,71 @@ TEST(Adapting, LeavesABlockOnASideAtRest)
       EXPECT_EQ(run.points().size, 4 * n_points);
       EXPECT_LT(run.totals().all.kinetic_energy, 1e-20);
     }
+}
+
+
+
+// Parts of a point near the edge of a cell lie in the next one: where their
+// domains overlapped, others would leave gaps, and bodies under stress creep.
+TEST(Splitting, DomainsOfPartsFillThatOfTheWhole)
+{
+  for (const std::string kernel : {"cpdi", "gimp"})
+    {
+      SCOPED_TRACE(kernel);
+      SceneRun<2>          run(block<2>("set Lower corner = 3, 3"),
+                      {"Method/Kernel=" + kernel,
+                                "Method/Stress update=usl",
+                                "Body block/Locking treatment=none",
+                                "Body block/Placement=regular"});
+      dealii::Tensor<1, 2> shift;
+      shift[0] = 0.1;
+      shift[1] = 0.07;
+      run.translate(shift);
+      constexpr double   half    = 0.125; // edge of a domain
+      MaterialPoints<2> &points  = run.bodies[0]->points;
+      const std::size_t  n       = points.size();
+      std::size_t        n_apart = 0;
+      for (std::size_t p = 0; p < n; ++p)
+        {
+          const dealii::Point<2>   whole = run.position(p);
+          const std::uint32_t      cell  = points.view().cell[p];
+          std::vector<std::size_t> all   = {p};
+          for (std::size_t q = 0; q < 3; ++q)
+            all.push_back(points.size() + q);
+          points.split({p}, 2, {{0, 0}}, points.size());
+          for (const std::size_t q : all)
+            {
+              const auto way = run.position(q) - whole;
+              const auto xi =
+                natural_place(points.view(),
+                              run.grid.geometry[points.view().cell[q]],
+                              q);
+              for (int d = 0; d < 2; ++d)
+                {
+                  EXPECT_NEAR(std::abs(way[d]), 0.5 * half, 1e-14);
+                  EXPECT_NEAR(points.view().domain[3 * d][q],
+                              0.5 * half,
+                              1e-14);
+                  EXPECT_GE(xi[d], 0);
+                  EXPECT_LE(xi[d], 1);
+                }
+              n_apart += points.view().cell[q] != cell;
+            }
+        }
+      EXPECT_GT(n_apart, 0u);
+    }
+}
+
+
+
+// The cells with points limit the steps, not finer ones further on.
+TEST(Adapting, EmptyFineCellsDoNotCountInTheCourantNumber)
+{
+  SceneRun<2> apart(block<2>("set Lower corner = 3, 3")),
+    inside(block<2>("set Upper corner = 1, 1"));
+  EXPECT_EQ(apart.grid.smallest_edge, 0.25);
+  EXPECT_EQ(smallest_edge_with_points(apart.state()), 0.5);
+  EXPECT_EQ(smallest_edge_with_points(inside.state()), 0.25);
 }
 
 

@@ -230,6 +230,23 @@ namespace limber::test
 
 
 
+  // The loads of a bar that creeps go on working, and no energy is missing. Of
+  // a ball that turns as much is in tension.
+  TEST(Health, CreepOfBarsUnderTensionIsBad)
+  {
+    HealthFigures figures       = sound();
+    BodyFigures  &body          = figures.bodies[0];
+    body.crossings_under_strain = 30;
+    body.share_in_tension       = 0.78;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::look);
+    figures.loads = 2 * body.strain_energy;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::bad);
+    body.share_in_tension = 0.5; // it bends
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::look);
+  }
+
+
+
   // The balance does not miss plastic work.
   TEST(Health, CreepOfWhatFlowsInTensionIsBad)
   {

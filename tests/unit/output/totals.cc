@@ -159,6 +159,41 @@ namespace limber::test
 
 
 
+  /** A body in free fall, which nothing strains: the last step is a short one,
+   * and its half is not what the potential leaves open. */
+  TEST(Totals, FreeFallIsJudgedByWhatGravityGave)
+  {
+    SampleRun<2> run(false);
+    run.problem.loads.gravity[1] = -10;
+    run.problem.method.order     = StressUpdateOrder::musl;
+    Balance<2>   balance(run.state);
+    PointView<2> points = run.points().view();
+    for (const double step : {0.01, 0.01, 0.01, 0.01, 0.01, 0.002})
+      {
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            points.velocity[1][p] -= 10 * step;
+            points.position[1][p] += step * points.velocity[1][p];
+          }
+        ++run.state.step;
+        run.state.time += step;
+        run.state.step_size = step;
+      }
+    const double of_fall = 0.5 * 500 * 0.52 * 0.52;
+    Totals<2>    totals  = balance.evaluate(run.state);
+    EXPECT_NEAR(totals.all.kinetic_energy, of_fall, 1e-10);
+    EXPECT_LT(std::abs(totals.unexplained_energy), 1e-12 * of_fall);
+    EXPECT_NEAR(balance.state().inner_scale, 0.01 * of_fall, 1e-10);
+
+    // and what is missing is still told
+    for (std::size_t p = 0; p < points.size; ++p)
+      points.velocity[1][p] *= 0.9;
+    totals = balance.evaluate(run.state);
+    EXPECT_LT(totals.unexplained_energy, -balance.state().inner_scale);
+  }
+
+
+
   /** Tractions that pull at two ends have no sum but round-off. */
   TEST(Totals, RoundOffOfLoadsInBalanceIsNoErrorOfMomentum)
   {

@@ -747,6 +747,42 @@ TEST(Choices, RotationInTheCurrentFrameIsTold)
 
 
 
+// Linear functions that the scene asks for creep, whatever the transfer.
+TEST(Choices, CreepOfLinearFunctionsIsTold)
+{
+  const auto told = [](std::vector<std::string> changes,
+                       const bool               is_loaded = true) {
+    if (is_loaded)
+      changes.insert(changes.begin(),
+                     {"Loads/Face loads=pull",
+                      "Loads/Face load pull/Body=block",
+                      "Loads/Face load pull/Face=right",
+                      "Loads/Face load pull/Traction=1; 0"});
+    changes.insert(changes.begin(),
+                   {"Body block/Frame=current",
+                    "Body block/Initial velocity=3; 0",
+                    "Grid/Cells=10, 10",
+                    "End time=1",
+                    "Method/Kernel=linear"});
+    const auto notes = read(changes).notes;
+    return std::any_of(notes.begin(), notes.end(), [](const auto &note) {
+      return note.find("'block' is under load") != std::string::npos &&
+             note.find("creeps") != std::string::npos &&
+             note.find("'Method/Kernel = quadratic'") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(told({}));
+  EXPECT_TRUE(told({"Method/Transfer=apic"}));
+  EXPECT_TRUE(told({"Method/Transfer=fmpm"}));
+  EXPECT_FALSE(told({"Method/Kernel=quadratic"}));
+  EXPECT_FALSE(told({"Method/Kernel=auto"}));
+  EXPECT_FALSE(told({"Body block/Frame=initial"}));
+  EXPECT_FALSE(told({"Body block/Initial velocity=0.01; 0"}));
+  EXPECT_FALSE(told({}, /*is_loaded=*/false));
+}
+
+
+
 // At first order in the step 'usavg' spins it up.
 TEST(Choices, SpinFromTheStressUpdateIsTold)
 {

@@ -593,8 +593,9 @@ TEST(Scenes, LiquidsBesideObstaclesAreCut)
   };
   EXPECT_EQ(placement("0.73, 0.5", true), Placement::cut);
   EXPECT_EQ(placement("0.6875, 0.5", true), Placement::regular);
-  EXPECT_EQ(placement("0.73, 0.5", false), Placement::cut); // 2.7 % off
-  EXPECT_EQ(placement("0.75, 0.51", false), Placement::regular);
+  EXPECT_EQ(placement("0.73, 0.5", false), Placement::cut);  // 2.7 % off
+  EXPECT_EQ(placement("0.75, 0.51", false), Placement::cut); // 2 % off
+  EXPECT_EQ(placement("0.75, 0.5003", false), Placement::regular);
   EXPECT_EQ(placement("0.6875, 0.5", true, 1), Placement::regular);
   EXPECT_EQ(placement("0.71875, 0.5", true, 1), Placement::cut);
   EXPECT_EQ(placement("0.75, 0.51", false, 1), Placement::cut);
