@@ -332,12 +332,9 @@ namespace limber
     // In a leapfrog scheme velocities belong to the middle of a step and places
     // to its end, which leaves this part of the potential undetermined: a fall
     // from rest would seem to lose 1 / (2 n + 1) of its energy after n steps.
-    // The last step may be shorter than those that gave the momentum.
-    const double mean_of_former =
-      state.step > 1 ? (state.time - state.step_size) / (state.step - 1.) : 0;
     const double of_half_a_step =
       moves_by_new_velocity(state.problem.method) ?
-        0.5 * std::max(state.step_size, mean_of_former) *
+        0.5 * state.step_size *
           std::abs(state.problem.loads.gravity * impulse) :
         0;
     const double unknown      = round_off + of_half_a_step;

@@ -409,36 +409,6 @@ namespace limber
 
 
 
-  namespace
-  {
-    /**
-     * Splines at a position near a cell: in the cell their values, beyond it
-     * the tangent planes of its nearest face, where functions that end there
-     * remain zero.
-     */
-    template <int dim>
-    Support<dim>
-    tangent_support(const GridView<dim>      &grid,
-                    const std::uint32_t       cell,
-                    const dealii::Point<dim> &place)
-    {
-      const CellGeometry<dim> &geometry = grid.cells[cell];
-      std::array<double, dim>  nearest;
-      for (int d = 0; d < dim; ++d)
-        nearest[d] =
-          std::clamp(place[d],
-                     geometry.origin[d],
-                     geometry.origin[d] + 1 / geometry.inverse_edge[d]);
-      Support<dim> result = support_at<dim>(grid, cell, nearest);
-      for (int i = 0; i < result.n; ++i)
-        for (int d = 0; d < dim; ++d)
-          result.value[i] += result.gradient[i][d] * (place[d] - nearest[d]);
-      return result;
-    }
-  } // namespace
-
-
-
   template <int dim>
   Support<dim>
   support_of_piece(const GridView<dim>  &grid,
@@ -466,23 +436,7 @@ namespace limber
             return result;
           }
       }
-    dealii::Tensor<1, dim> arm = pull_back(points, p) * piece.arm;
-    // The carrier's material reaches from the face to as deep below the point:
-    // V_p sigma grad N is balanced by A t (depth . grad N).
-    if ((grid.quadratics || grid.cubics) && !points.in_initial_frame())
-      {
-        const dealii::Tensor<1, dim> area   = piece.area_vector();
-        const double                 height = piece.arm * area / area.norm();
-        if (height > 0)
-          {
-            const dealii::Tensor<1, dim> depth = height / area.norm() * area;
-            dealii::Point<dim>           inner;
-            for (int d = 0; d < dim; ++d)
-              inner[d] = points.position[d][p] - depth[d];
-            result.value = tangent_support(grid, points.cell[p], inner).value;
-            arm += depth;
-          }
-      }
+    const dealii::Tensor<1, dim> arm = pull_back(points, p) * piece.arm;
     for (int i = 0; i < result.n; ++i)
       for (int d = 0; d < dim; ++d)
         result.value[i] += result.gradient[i][d] * arm[d];

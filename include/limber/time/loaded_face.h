@@ -98,10 +98,7 @@ namespace limber
    * shares of a force on the piece as values. In the initial frame these are
    * the functions at the place where the piece was at the start, if that is in
    * the cell of its carrier; else the functions at the carrier and their
-   * gradients times the arm. With splines in the current frame they are the
-   * functions as deep below the carrier as the piece is above it, and the
-   * gradients at the carrier times the way from there: nodes that feel no more
-   * than the stress of the carrier then get what holds this stress.
+   * gradients times the arm.
    */
   template <int dim>
   Support<dim>

@@ -168,7 +168,8 @@ namespace limber::test
     run.problem.method.order     = StressUpdateOrder::musl;
     Balance<2>   balance(run.state);
     PointView<2> points = run.points().view();
-    for (const double step : {0.01, 0.01, 0.01, 0.01, 0.01, 0.002})
+    constexpr double step = 0.01;
+    for (int n = 0; n < 6; ++n)
       {
         for (std::size_t p = 0; p < points.size; ++p)
           {
@@ -179,7 +180,7 @@ namespace limber::test
         run.state.time += step;
         run.state.step_size = step;
       }
-    const double of_fall = 0.5 * 500 * 0.52 * 0.52;
+    const double of_fall = 0.5 * 500 * 0.6 * 0.6;
     Totals<2>    totals  = balance.evaluate(run.state);
     EXPECT_NEAR(totals.all.kinetic_energy, of_fall, 1e-10);
     EXPECT_LT(std::abs(totals.unexplained_energy), 1e-12 * of_fall);

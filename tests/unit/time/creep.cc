@@ -232,8 +232,7 @@ TEST(Creep, OfBoxesIsSmall)
 
 
 // Their domains fill the former one. Where they did not, the bar grew by 38 and
-// 15 %; now by 2 and 4 %, as corners of parts lie between those of whole
-// points.
+// 15 %; now by 2 and 4 %.
 TEST(Creep, OfDomainsThatAreSplitIsSmall)
 {
   EXPECT_LT(std::abs(growth_of_split_points("cpdi")), 0.05);
