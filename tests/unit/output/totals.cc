@@ -166,9 +166,9 @@ namespace limber::test
     SampleRun<2> run(false);
     run.problem.loads.gravity[1] = -10;
     run.problem.method.order     = StressUpdateOrder::musl;
-    Balance<2>   balance(run.state);
-    PointView<2> points = run.points().view();
-    constexpr double step = 0.01;
+    Balance<2>       balance(run.state);
+    PointView<2>     points = run.points().view();
+    constexpr double step   = 0.01;
     for (int n = 0; n < 6; ++n)
       {
         for (std::size_t p = 0; p < points.size; ++p)
