@@ -57,6 +57,28 @@ namespace limber
 
 
 
+    /** Call work(place) for the places inside a body of a lattice of n^dim in
+     * its bounding box. */
+    template <int dim, class Work>
+    void
+    for_each_sample(const Body<dim>   &body,
+                    const unsigned int n,
+                    const Work        &work)
+    {
+      const Corners<dim> box = body.shape->bounding_box();
+      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
+        {
+          dealii::Point<dim> place;
+          for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
+            place[d] = box.first[d] +
+                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
+          if (body.shape->contains(place))
+            work(place);
+        }
+    }
+
+
+
     /**
      * Cells that the mean initial velocity of a body carries it past until the
      * end, if nothing stops it. Sampled on a lattice.
@@ -67,21 +89,12 @@ namespace limber
     {
       if (body.initial_velocity.empty())
         return 0;
-      constexpr unsigned int n   = 8;
-      const Corners<dim>     box = body.shape->bounding_box();
       dealii::Tensor<1, dim> sum;
       double                 count = 0;
-      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
-        {
-          dealii::Point<dim> place;
-          for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
-            place[d] = box.first[d] +
-                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
-          if (!body.shape->contains(place))
-            continue;
-          sum += body.initial_velocity.vector(place, 0);
-          ++count;
-        }
+      for_each_sample(body, 8, [&](const dealii::Point<dim> &place) {
+        sum += body.initial_velocity.vector(place, 0);
+        ++count;
+      });
       double result = 0;
       for (unsigned int d = 0; d < dim && count > 0; ++d)
         result = std::max(result,
@@ -152,24 +165,16 @@ namespace limber
     {
       if (body.initial_velocity.empty())
         return 0;
-      constexpr unsigned int              n   = dim == 2 ? 24 : 10;
-      const Corners<dim>                  box = body.shape->bounding_box();
       std::vector<dealii::Point<dim>>     places;
       std::vector<dealii::Tensor<1, dim>> velocities;
       dealii::Tensor<1, dim>              place_sum, velocity_sum;
-      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
-        {
-          dealii::Point<dim> place;
-          for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
-            place[d] = box.first[d] +
-                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
-          if (!body.shape->contains(place))
-            continue;
+      for_each_sample(
+        body, dim == 2 ? 24 : 10, [&](const dealii::Point<dim> &place) {
           places.push_back(place);
           velocities.push_back(body.initial_velocity.vector(place, 0));
           place_sum += place;
           velocity_sum += velocities.back();
-        }
+        });
       std::array<double, 3> momentum{};
       double                squares = 0; // of the distance from the centre
       for (std::size_t i = 0; i < places.size(); ++i)
