@@ -30,8 +30,6 @@ namespace limber
 
 
 
-  // The law knows the stretch of a pack of points; what points keep themselves
-  // is looked at one by one.
   template <int dim>
   void
   stretches_along(const MaterialBody<dim>               &body,

@@ -52,7 +52,7 @@ namespace limber
 
 
 
-  /** The same for n points, see StressUpdate::stretches_along(). */
+  /** The same for n points, @p which of the body; directions by component. */
   template <int dim>
   void
   stretches_along(const MaterialBody<dim>               &body,
